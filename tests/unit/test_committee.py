@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import torch
@@ -61,9 +63,10 @@ def test_shares_are_the_geometric_mean_of_the_members() -> None:
     seen = train.inputs[:, 0, 0].astype(np.float64)
     even = np.clip((seen - seen.mean(axis=0)) / seen.std(axis=0, ddof=1), -MOST, MOST)
     votes = np.zeros((40, 3))
+    layers: list[Any] = list(committee.layers)
     for member in range(MEMBERS):
         values = even
-        for number, layer in enumerate(committee.layers):
+        for number, layer in enumerate(layers):
             weight, bias = (each.detach().numpy()[member] for each in (layer.weight, layer.bias))
             values = values @ weight + bias
             values = np.maximum(values, 0.0) if number < 2 else values

@@ -158,8 +158,9 @@ def _drawn(seen: np.ndarray, net: Net) -> np.ndarray:
 
 def _made(details: Mapping[str, Any]) -> list[tuple[str, Any]]:
     """What the numbers rest on."""
-    plain = ("device", "look", "parameters", "recipe", "design", "code", "program")
+    plain = ("device", "look", "recipe", "design", "code", "program")
     rows: list[tuple[str, Any]] = [(name, details[name]) for name in plain]
+    rows.append(("parameters", f"{details['parameters']:,}"))
     rows += [(f"learning: {name}", value) for name, value in details["learning"].items()]
     rows += [(f"time of {name} [s]", value) for name, value in details["seconds"].items()]
     for part in ("twin", "calibration", "trained_on_photos"):

@@ -28,7 +28,7 @@ from workbench.project.project import Project
 if TYPE_CHECKING:
     from workbench.learning.dataset.images import Cameras
 
-LEFT = 0.3
+LEFT_BY_CALIBRATION = 0.3
 """Of what light and camera are off by chance, what a calibration leaves: our choice."""
 
 
@@ -37,7 +37,7 @@ def known_looks(before: Looks) -> Looks:
     return Looks(
         count=before.count,
         **{
-            item.name: LEFT * getattr(before, item.name)
+            item.name: LEFT_BY_CALIBRATION * getattr(before, item.name)
             for item in dataclasses.fields(before)
             if item.name != "count"
         },
