@@ -54,7 +54,7 @@ class Examples:
     motion: np.ndarray
     """Of windows, over the width of the image, shape (N,)."""
     features: np.ndarray | None = None
-    """What a network that does not learn has seen, shape (N, 1 + copies, T, F), float16."""
+    """What a network that does not learn has seen, shape (N, 1 + copies, T, F), of 16 or 32 bit."""
     truth: np.ndarray
     """Number of the class, shape (N,), int64; or values, shape (N, K), float64."""
     outputs: tuple[str, ...]

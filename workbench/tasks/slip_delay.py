@@ -1,7 +1,8 @@
 """How late slip is told, and how well it is told from the time alone.
 
 A slide is told to slip in the first frame in which the window that ends there is. The delay is
-counted from the first frame in which 95 % of the contact slides; a negative one is a false alarm.
+counted from the first window at whose end 95 % of the contact slides; a negative one is a false
+alarm. Where windows are left out, it is known to so many frames.
 
 In renders every slide is pressed and dragged in the same steps, so that a window slips the more
 likely the later it is. What a threshold on the number of its last frame tells stands beside what

@@ -22,6 +22,8 @@ from workbench.twin.draw import FRICTION, LEAST_FRICTION
 CASES = {Size.SMALL: 24, Size.PAPER: 500}
 WINDOWS = {Size.SMALL: 80, Size.PAPER: 832}
 """At most: a slide that comes to slip gives two."""
+MOST_FRICTION = 2.0
+"""Of a recipe."""
 SIZES_MM = {Size.SMALL: (5.0, 8.0), Size.PAPER: (3.0, 12.0)}
 
 
@@ -39,7 +41,8 @@ def recipe(design: SensorDesign, size: Size) -> Recipe:
         sequences=WINDOWS[size],
     )
     about = design.material.friction
-    friction = max(LEAST_FRICTION, round(about - FRICTION, 6)), round(about + FRICTION, 6)
+    least = max(LEAST_FRICTION, round(about - FRICTION, 6))
+    friction = least, min(MOST_FRICTION, round(about + FRICTION, 6))
     vary = dataclasses.replace(made.vary, friction=friction)
     return dataclasses.replace(made, cases=CASES[size], vary=vary)
 

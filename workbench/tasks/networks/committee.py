@@ -29,6 +29,10 @@ SETTINGS = {
     "decay": DECAY,
     "noise": NOISE,
     "members": MEMBERS,
+    "hidden": HIDDEN,
+    "dropout": DROPOUT,
+    "most": MOST,
+    "smoothing": SMOOTHING,
 }
 """How it learns, as results tell it."""
 
@@ -47,8 +51,9 @@ class Committee(nn.Module):
             part: What it learns from: middle and spread of all it sees become 0 and 1.
         """
         super().__init__()
+        self.outputs = outputs
         seen = torch.as_tensor(part.inputs[:, 0, 0]).float()
-        spread = seen.std(dim=0)
+        spread = seen.std(dim=0, correction=0)
         self.register_buffer("middle", seen.mean(dim=0))
         self.register_buffer("spread", torch.where(spread > 0.0, spread, 1.0))
         sizes = (seen.shape[1], HIDDEN, HIDDEN, outputs)
@@ -97,7 +102,7 @@ def learn_committee(
     Args:
         committee: On the device where it learns.
         parts: What it learns from, and what tells how far it came.
-        seed: Of what is drawn.
+        seed: Of examples and noise; what drops out goes by the generator of torch.
         monitor: Progress and cancellation.
 
     Raises:
@@ -107,8 +112,8 @@ def learn_committee(
     device = committee.middle.device
     even = committee.even(torch.as_tensor(train.inputs[:, 0, 0], device=device).float())
     truth = torch.as_tensor(train.truth, device=device)
-    often = torch.bincount(truth).clamp(min=1).float()
-    balance = len(truth) / (len(often) * often)
+    often = torch.bincount(truth, minlength=committee.outputs)
+    balance = (1.0 / often.clamp(min=1).float())[truth]
     generator = torch.Generator(device=device).manual_seed(seed)
     optimiser = torch.optim.AdamW(committee.parameters(), lr=RATE, weight_decay=DECAY)
     rates = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=STEPS)
@@ -119,9 +124,15 @@ def learn_committee(
         rows = torch.randint(len(truth), shape, generator=generator, device=device)
         noise = torch.randn((*shape, even.shape[1]), generator=generator, device=device)
         votes = committee.votes(even[rows] + NOISE * noise)
-        loss = nn.functional.cross_entropy(
-            votes.flatten(0, 1), truth[rows].flatten(), weight=balance, label_smoothing=SMOOTHING
+        # Weights of classes would weigh what smoothing adds as well, and tell rare ones too often.
+        each = nn.functional.cross_entropy(
+            votes.flatten(0, 1),
+            truth[rows].flatten(),
+            label_smoothing=SMOOTHING,
+            reduction="none",
         )
+        weight = balance[rows].flatten()
+        loss = (each * weight).sum() / weight.sum()
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()

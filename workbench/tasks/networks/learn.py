@@ -40,7 +40,7 @@ class Part:
 
     inputs: np.ndarray
     """What is seen [grey level], shape (N, T, h, w, 3), int16; or features and those of varied
-    copies, shape (N, 1 + copies, T, F), float16."""
+    copies, shape (N, 1 + copies, T, F), of 16 or 32 bit."""
     at: np.ndarray
     """Where and how strong it is, shape (N, 8), float32."""
     truth: np.ndarray

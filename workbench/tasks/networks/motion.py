@@ -16,8 +16,10 @@ import itertools
 
 import numpy as np
 
-MIDDLE = 5 / 16, 11 / 16
-"""Beginning and end of the middle of a patch, over its side."""
+from workbench.tasks.networks.in_sight import filled, mean_over, pixels_in_sight
+
+MIDDLE = 3 / 16
+"""Half the side of the middle of a patch, over its side."""
 RINGS = (0.0, 0.14, 0.25, 0.375, 0.56)
 """Radii between which rings lie, over the side of a patch."""
 LEAST_MM, NO_WAY_MM = 0.004, 1e-6
@@ -37,24 +39,24 @@ def motion_numbers(window: np.ndarray, mm_per_px: float) -> np.ndarray:
         window: Images [grey level], shape (T, S, S, 3).
         mm_per_px: Size of a pixel on the skin [mm].
     """
-    grey = np.clip(window.mean(axis=3), 0, 255).astype(np.uint8)
+    pixels = pixels_in_sight(window)
+    grey = np.clip(filled(window, pixels).mean(axis=3), 0, 255).astype(np.uint8)
     steps = mm_per_px * np.stack([_flow_px(*pair) for pair in itertools.pairwise(grey)])
     ways = mm_per_px * np.stack([_flow_px(grey[0], after) for after in grey[1:]])
-    step, way = together(steps), together(ways)
+    seen = _cells(pixels.astype(np.float64)) > 0.5
+    seen = seen if seen.any() else ~seen
+    middle, *rings = _regions(len(seen))
+    step, way = (mean_over(flows, middle, seen) for flows in (steps, ways))
     whole = way[-1] / (np.linalg.norm(way[-1]) + NO_WAY_MM)
     along = step @ whole
-    numbers = [*_lengths(steps), *_lengths(ways), along / USUAL_MM, way @ whole]
-    numbers.append(along / (np.abs(along).max() + LEAST_MM))
-    for ring in _rings(steps.shape[1]):
-        inside = steps[:, ring]
-        numbers.append(np.log(np.linalg.norm(inside, axis=2).mean(axis=1) + LEAST_MM))
-        numbers.append(inside.mean(axis=1) @ whole / USUAL_MM)
+    numbers = [np.log(each + LEAST_MM) for each in _lengths_mm(steps, middle, seen)]
+    numbers += [np.log(each + LEAST_MM) for each in _lengths_mm(ways, middle, seen)]
+    numbers += [along / USUAL_MM, way @ whole, along / (np.abs(along).max() + LEAST_MM)]
+    length = np.linalg.norm(steps, axis=3)
+    for ring in rings:
+        numbers.append(np.log(mean_over(length, ring, seen) + LEAST_MM))
+        numbers.append(mean_over(steps, ring, seen) @ whole / USUAL_MM)
     return np.concatenate(numbers)
-
-
-def together(flows: np.ndarray) -> np.ndarray:
-    """Mean way in the middle of flows (N, C, C, 2), shape (N, 2)."""
-    return _middle(flows).mean(axis=(1, 2))
 
 
 def _flow_px(before: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -73,29 +75,33 @@ def _flow_px(before: np.ndarray, after: np.ndarray) -> np.ndarray:
         SMOOTH_PX,
         0,
     )
-    cells = len(before) // CELL_PX
-    return flow.reshape(cells, CELL_PX, cells, CELL_PX, 2).mean(axis=(1, 3), dtype=np.float64)
+    return _cells(flow)
 
 
-def _lengths(flows: np.ndarray) -> list[np.ndarray]:
+def _cells(pixels: np.ndarray) -> np.ndarray:
+    """Means of pixels (S, S, ...) over squares, shape (C, C, ...)."""
+    cells = len(pixels) // CELL_PX
+    squares = pixels.reshape(cells, CELL_PX, cells, CELL_PX, *pixels.shape[2:])
+    return squares.mean(axis=(1, 3), dtype=np.float64)
+
+
+def _lengths_mm(
+    flows: np.ndarray, middle: np.ndarray, seen: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of flows (N, C, C, 2): mean length in the middle and all over, length of the mean in the
-    middle, as logarithms (N,)."""
+    middle, shapes (N,)."""
     length = np.linalg.norm(flows, axis=3)
-    found = (
-        _middle(length).mean(axis=(1, 2)),
-        length.mean(axis=(1, 2)),
-        np.linalg.norm(together(flows), axis=1),
+    return (
+        mean_over(length, middle, seen),
+        mean_over(length, seen, seen),
+        np.linalg.norm(mean_over(flows, middle, seen), axis=1),
     )
-    return [np.log(each + LEAST_MM) for each in found]
 
 
-def _middle(cells: np.ndarray) -> np.ndarray:
-    middle = slice(*(round(share * cells.shape[1]) for share in MIDDLE))
-    return cells[:, middle, middle]
-
-
-def _rings(cells: int) -> list[np.ndarray]:
-    """Which cells lie in each ring, shapes (C, C), bool."""
+def _regions(cells: int) -> list[np.ndarray]:
+    """Which cells lie in the middle, and in each ring, shapes (C, C), bool."""
     steps = (np.arange(cells) + 0.5) / cells - 0.5
-    radius = np.hypot(*np.meshgrid(steps, steps))
-    return [(radius >= low) & (radius < high) for low, high in itertools.pairwise(RINGS)]
+    across, down = np.meshgrid(steps, steps)
+    radius = np.hypot(across, down)
+    middle = np.maximum(np.abs(across), np.abs(down)) < MIDDLE
+    return [middle, *((radius >= low) & (radius < high) for low, high in itertools.pairwise(RINGS))]
