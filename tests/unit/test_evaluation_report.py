@@ -356,3 +356,11 @@ def test_only_the_room_forces_takes_data() -> None:
     assert set(validate.with_data("forces", Path("x"))) == set(validate.ROOMS)
     with pytest.raises(DesignError, match="measures on no data set"):
         validate.with_data("optics", Path("x"))
+
+
+def test_ways_keep_their_stroke_and_others_have_one_each() -> None:
+    """A chart that lacks a way draws the next as all charts do; what is no way goes by order."""
+    two = charts.lines("t", ["a"], {"learned": [1.0], "zero": [2.0]}, below="")
+    assert charts.STROKES[2][0] in two and charts.STROKES[1][0] not in two
+    own = charts.bars("t", ["a"], {"here": [1.0], "there": [2.0]}, below="")
+    assert charts.STROKES[0][0] in own and charts.STROKES[1][0] in own

@@ -10,10 +10,12 @@ import numpy as np
 
 from workbench.learning.evaluation.charts import lines
 from workbench.report import html_page
+from workbench.tasks.features import ON_FEATURES
+from workbench.tasks.networks import committee, dent, head
 from workbench.tasks.networks.patch import DENT
 from workbench.tasks.outcome import WORDS, Failure, Row, Tested
 from workbench.tasks.run import Result
-from workbench.tasks.task import Net, Told, task_of
+from workbench.tasks.task import Net, Task, Told, task_of
 
 CHANGED = "as differences from rest, twice as strong", 128, 2
 DENTS = (Net.DENT, Net.MEASURES)
@@ -22,6 +24,9 @@ SEEN = {
     Net.MOTION: ("the last image, laid flat", 0, 1),
 }
 """What networks are shown, in words, with the grey level of nothing and the gain it is drawn by."""
+TOLD_EVERY = {Net.DENT: dent.TOLD_EVERY, Net.MOTION: committee.TOLD_EVERY}
+"""Steps between two points of the curve of networks that count no epochs."""
+LEFT = {Told.CLASS: "share of the validation part told wrong", Told.VALUES: "error in validation"}
 CURVE_POINTS = 12
 SHOWN_PX = 220
 
@@ -45,7 +50,7 @@ def report_page(result: Result, table: Mapping[str, Any]) -> str:
     if task.formula:
         body.append(f"<p>{html.escape(f'safety = {task.formula}')}.</p>")
     for test in result.tests:
-        body += _test(test, task.told, result.plan.net)
+        body += _test(test, task, result.plan.net)
     body.append("<h2>How it was made</h2>")
     body.append(html_page.table(_made(details)))
     return html_page.page(title, "".join(body))
@@ -76,13 +81,13 @@ def _test_of(row: Row) -> Any:
     return next(test for test in WORDS if test.value == row.test)
 
 
-def _test(test: Tested, told: Told, net: Net) -> list[str]:
+def _test(test: Tested, task: Task, net: Net) -> list[str]:
     """Everything about one test."""
     parts = [f"<h2>{html.escape(WORDS[test.test])}</h2>"]
     details = test.details
     counts = ", ".join(map(str, details["tested_on"]))
     parts.append(f"<p>Tested on {counts} examples, seed by seed.</p>")
-    if told is Told.CLASS:
+    if task.told is Told.CLASS:
         parts.append(_confusion(details["outputs"], np.array(details["confusion"])))
     else:
         ranks = details["rank_correlation"].items()
@@ -98,7 +103,7 @@ def _test(test: Tested, told: Told, net: Net) -> list[str]:
         delay = details["delay"]
         told_of = [(name.replace("_", " "), str(value)) for name, value in delay.items()]
         parts.append(f"<h3>Delay of slip</h3>{html_page.table(told_of)}")
-    parts.append(_curves(details["seeds"]))
+    parts.append(curves(details["seeds"][0]["curve"], task.told, net))
     parts.append(_gallery(test.failures, net))
     return parts
 
@@ -122,17 +127,22 @@ def _shade(share: float) -> str:
     return f"rgb(31 111 235 / {100.0 * share:.0f}%)"
 
 
-def _curves(seeds: Sequence[Mapping[str, Any]]) -> str:
-    """Loss of both parts over the epochs, or over penalties, of the first seed."""
-    curve = seeds[0]["curve"]
+def curves(curve: Sequence[Mapping[str, float]], told: Told, net: Net) -> str:
+    """What a training had come to after each epoch, some steps, or with each penalty."""
     if len(curve) < 2:
         return ""
+    names, below = [str(k + 1) for k in range(len(curve))], "epoch"
+    if net in TOLD_EVERY:
+        below = f"{TOLD_EVERY[net]} steps each"
+    elif net in ON_FEATURES:
+        names, below = [f"{each:g}" for each in head.PENALTIES], "penalty of the regression"
     shown = np.unique(np.linspace(0, len(curve) - 1, CURVE_POINTS).astype(int))
+    series = {"loss of training": "train", LEFT[told]: "validation"}
     return lines(
-        "Loss of the first seed",
-        [str(k + 1) for k in shown],
-        {name: [curve[k][name] for k in shown] for name in ("train", "validation")},
-        below="epoch, or penalty of a regression",
+        "How the first seed learned",
+        [names[k] for k in shown],
+        {words: [curve[k][name] for k in shown] for words, name in series.items()},
+        below=below,
     )
 
 

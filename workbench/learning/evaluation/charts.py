@@ -12,9 +12,10 @@ from workbench.report.plot_axis import FAINT, INK, LINE, Axis, tick_text
 
 WIDTH, HEIGHT = 480, 270
 LEFT, RIGHT, TOP, BOTTOM = 66, 12, 34, 76
-COLOURS = {"learned": LINE, "mpm": "#b45309", "zero": "#8b93a0"}
-"""Of the three ways; told apart in grey as well, as each line has its own dashes."""
-DASHES = {"learned": "", "mpm": "6 3", "zero": "2 3"}
+STROKES = ((LINE, ""), ("#b45309", "6 3"), ("#8b93a0", "2 3"))
+"""Colours of lines; told apart in grey as well, as each has its own dashes."""
+WAYS = ("learned", "mpm", "zero")
+"""Those of an evaluation have the same stroke on every chart; others go by their order."""
 WORDS = {"mpm": "contact solver"}
 BINS = 12
 LETTER_PX = 6.0
@@ -37,14 +38,14 @@ def lines(
     step = (WIDTH - LEFT - RIGHT) / max(len(names), 1)
     places = [LEFT + step * (number + 0.5) for number in range(len(names))]
     drawn = []
-    for way, values in series.items():
+    for number, (way, values) in enumerate(series.items()):
         known = [(x, v) for x, v in zip(places, values, strict=True) if math.isfinite(v)]
         points = " ".join(f"{x:.1f},{up(value):.1f}" for x, value in known)
         dots = "".join(
             f"<circle cx='{x:.1f}' cy='{up(value):.1f}' r='3'><title>{value:.4g}</title></circle>"
             for x, value in known
         )
-        colour, dash = COLOURS.get(way, INK), DASHES.get(way, "")
+        colour, dash = _stroke(way, number)
         drawn.append(
             f"<polyline points='{points}' fill='none' stroke='{colour}' stroke-width='2' "
             f"stroke-dasharray='{dash}'/><g fill='{colour}'>{dots}</g>"
@@ -63,10 +64,10 @@ def bars(
     places = [LEFT + step * (number + 0.5) for number in range(len(names))]
     drawn = []
     for number, (way, values) in enumerate(series.items()):
-        shift = (number - len(series) / 2.0) * width
+        shift, (colour, _) = (number - len(series) / 2.0) * width, _stroke(way, number)
         for place, value in zip(places, values, strict=True):
             if math.isfinite(value):
-                drawn.append(_bar(place + shift, width, up, value, COLOURS.get(way, LINE)))
+                drawn.append(_bar(place + shift, width, up, value, colour))
     inner = _names(names, places) + "".join(drawn) + _legend(list(series))
     return _chart(title, up, inner, below, slanted=len(names) >= SLANTED)
 
@@ -117,10 +118,15 @@ def _names(names: Sequence[str], places: Sequence[float]) -> str:
     return f"<g font-size='10' fill='{INK}'>{''.join(found)}</g>"
 
 
+def _stroke(way: str, number: int) -> tuple[str, str]:
+    """Colour and dashes of the line of a way, the `number`-th of its chart."""
+    return STROKES[(WAYS.index(way) if way in WAYS else number) % len(STROKES)]
+
+
 def _legend(ways: Sequence[str]) -> str:
     found, x = [], float(LEFT + 4)
-    for way in ways:
-        colour, dash = COLOURS.get(way, INK), DASHES.get(way, "")
+    for number, way in enumerate(ways):
+        colour, dash = _stroke(way, number)
         found.append(
             f"<path d='M{x:g},26 h22' stroke='{colour}' stroke-width='3' "
             f"stroke-dasharray='{dash}'/><text x='{x + 27:g}' y='30' font-size='11' "

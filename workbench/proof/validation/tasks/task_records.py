@@ -64,6 +64,7 @@ class TaskRecord:
                 "workbench.project",
                 "workbench.report",
                 "workbench.system",
+                "workbench.tasks.report",
                 "workbench.view",
             ),
         )
