@@ -157,6 +157,7 @@ def page(browser: Any) -> Iterator[Any]:
     tab = context.new_page()
     tab.set_default_timeout(60_000)
     yield tab
-    # Shown by pytest beside a test that failed.
-    print("the page showed", tab.evaluate("document.body.innerText"), sep="\n")
+    if not tab.is_closed():
+        # Shown by pytest beside a test that failed.
+        print("the page showed", tab.evaluate("document.body.innerText"), sep="\n")
     context.close()
