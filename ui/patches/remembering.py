@@ -3,7 +3,8 @@
 viser tells the server neither, and forgets both at a reload. The page keeps them itself in
 `localStorage`, once something was dragged or chosen, and puts them back once the docks stand: a
 width by a drag of the edge as the keyboard does it (`keyboard.py`), a tab by Enter. A width is put
-back as far as the timeline finds room between the docks.
+back as far as the timeline finds room between the docks; of tabs none, once a hand has chosen one
+before the docks stood. All of it happens once in a page.
 
 *Image size* is the width of the right dock, so it is remembered with that. Where a dock was moved
 to, or whether it is minimised, is not.
@@ -21,8 +22,12 @@ NARROW_PX = 576
 REMEMBER = """
 (() => {
   const before = window.keptDocks;
-  if (before) for (const name of ['pointerup', 'keyup'])
-    document.removeEventListener(name, before.later, true);
+  if (before) {
+    /* The page lays this script several times while its docks come. */
+    clearTimeout(before.waits);
+    for (const name of ['pointerup', 'keyup'])
+      document.removeEventListener(name, before.later, true);
+  }
   const regions = () => Object.fromEntries(['left', 'right'].map(side => {
     const found = document.querySelector(`[data-dock-region="${side}"]`);
     return [side, found ? Math.round(found.getBoundingClientRect().width) : 0];
@@ -49,24 +54,31 @@ REMEMBER = """
       if (kept[side] > 100 && Math.abs(more) > 2 && edge && window.dragEdge)
         window.dragEdge(edge, side === 'left' ? more : -more);
     }
-    for (const name of kept.tabs || []) {
+    for (const name of window.keptDocks.chosen ? [] : kept.tabs || []) {
       const tab = tabs().find(one => one.textContent.trim() === name);
       if (tab && tab.getAttribute('aria-selected') !== 'true')
         tab.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));
     }
     window.keptDocks.back = true;
+    if (window.keptDocks.chosen) keep();
   };
   let last = '', stood = 0;
   const wait = () => {
     const now = JSON.stringify(regions());
     stood = now === last && regions().left && regions().right ? stood + 1 : 0;
     last = now;
-    if (stood >= 2) put(); else setTimeout(wait, STAND);
+    if (stood >= 2) put(); else window.keptDocks.waits = setTimeout(wait, STAND);
   };
   let soon = 0;
-  const later = () => { clearTimeout(soon); soon = setTimeout(keep, 800); };
+  const later = event => {
+    const pushed = event.type === 'pointerup' || event.key === 'Enter' || event.key === ' ';
+    if (event.isTrusted && pushed && event.target.closest && event.target.closest('[role=tab]'))
+      window.keptDocks.chosen = true;
+    clearTimeout(soon); soon = setTimeout(keep, 800);
+  };
   for (const name of ['pointerup', 'keyup']) document.addEventListener(name, later, true);
-  window.keptDocks = {later, back: Boolean(before && before.back)};
+  const {back = false, chosen = false} = before || {};
+  window.keptDocks = {later, back, chosen};
   if (innerWidth > NARROW && !window.keptDocks.back) wait();
 })();
 """
