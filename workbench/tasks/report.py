@@ -15,7 +15,7 @@ from workbench.tasks.networks import committee, dent, head
 from workbench.tasks.networks.patch import DENT
 from workbench.tasks.outcome import WORDS, Failure, Row, Tested
 from workbench.tasks.run import Result
-from workbench.tasks.task import Net, Task, Told, task_of
+from workbench.tasks.task import Net, Told, task_of
 
 CHANGED = "as differences from rest, twice as strong", 128, 2
 DENTS = (Net.DENT, Net.MEASURES)
@@ -50,7 +50,7 @@ def report_page(result: Result, table: Mapping[str, Any]) -> str:
     if task.formula:
         body.append(f"<p>{html.escape(f'safety = {task.formula}')}.</p>")
     for test in result.tests:
-        body += _test(test, task, result.plan.net)
+        body += _test(test, task.told, result.plan.net)
     body.append("<h2>How it was made</h2>")
     body.append(html_page.table(_made(details)))
     return html_page.page(title, "".join(body))
@@ -81,13 +81,13 @@ def _test_of(row: Row) -> Any:
     return next(test for test in WORDS if test.value == row.test)
 
 
-def _test(test: Tested, task: Task, net: Net) -> list[str]:
+def _test(test: Tested, told: Told, net: Net) -> list[str]:
     """Everything about one test."""
     parts = [f"<h2>{html.escape(WORDS[test.test])}</h2>"]
     details = test.details
     counts = ", ".join(map(str, details["tested_on"]))
     parts.append(f"<p>Tested on {counts} examples, seed by seed.</p>")
-    if task.told is Told.CLASS:
+    if told is Told.CLASS:
         parts.append(_confusion(details["outputs"], np.array(details["confusion"])))
     else:
         ranks = details["rank_correlation"].items()
@@ -103,7 +103,7 @@ def _test(test: Tested, task: Task, net: Net) -> list[str]:
         delay = details["delay"]
         told_of = [(name.replace("_", " "), str(value)) for name, value in delay.items()]
         parts.append(f"<h3>Delay of slip</h3>{html_page.table(told_of)}")
-    parts.append(curves(details["seeds"][0]["curve"], task.told, net))
+    parts.append(curves(details["seeds"][0]["curve"], told, net))
     parts.append(_gallery(test.failures, net))
     return parts
 
