@@ -87,10 +87,7 @@ def test_two_variants_are_compared_and_the_report_opens_by_itself(
         page.wait_for_timeout(200)
     assert len(shown - {None}) >= 2
     choose(page, "Images", "side by side")
-    page.wait_for_timeout(1000)
-    still = blinking(page)
-    page.wait_for_timeout(1500)
-    assert blinking(page) == still, "it blinks on"
+    wait_until(lambda: rests(page), 20, "it no longer blinks")
 
     before = view(page)
     control(page, "Show B in 3D").click()
@@ -108,6 +105,13 @@ def test_two_variants_are_compared_and_the_report_opens_by_itself(
     assert [url for url in asked if not url.startswith(("data:", "file:"))] == []
     assert page.evaluate("window.hit") is None
     assert HOSTILE.split(">", maxsplit=1)[0] in page.locator("body").inner_text()
+
+
+def rests(page: Any) -> bool:
+    """Whether the large image stays the same for longer than a blink."""
+    now = blinking(page)
+    page.wait_for_timeout(1500)
+    return blinking(page) == now
 
 
 def blinking(page: Any) -> str | None:

@@ -19,6 +19,7 @@ from tests.ui.widgets import (
     open_page,
     set_number,
     slider_value,
+    switch,
     tab,
     type_text,
     wait_until,
@@ -93,7 +94,7 @@ def test_results_follow_by_themselves_once_edits_settle(
     server = start_server(pressed_project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
-    control(page, "Auto update").click(force=True)
+    switch(page, "Auto update")
     set_number(page, "Straight length mm", 24)
     set_number(page, "Elastomer mm", 2.4)
     wait_until(lambda: page.get_by_text("Image ○").count(), 20, "the image is stale")

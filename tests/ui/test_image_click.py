@@ -15,10 +15,10 @@ from tests.ui.widgets import (
     DRAW_WHEN_LOOKED_AT,
     VISIBLE_CHANGE,
     button,
-    control,
     looking,
     open_page,
     slider_value,
+    switch,
     wait_until,
 )
 
@@ -46,6 +46,12 @@ def click_pixel(page: Any, column: int, row: int, number: int = 0) -> None:
     x = box["width"] * (column + 0.5) / SIZE_PX[0]
     y = box["height"] * (row + 0.5) / SIZE_PX[1]
     page.mouse.click(box["x"] + x, box["y"] + y)
+
+
+def wait_for_probe(page: Any) -> None:
+    """Wait until clicks are taken: the server answers the box, and the page runs the answer."""
+    page.locator(".probe-image").wait_for(state="attached")
+    wait_until(lambda: page.evaluate("Boolean(window.probeImage)"), 20, "clicks are taken")
 
 
 class Told(NamedTuple):
@@ -109,8 +115,8 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     page.wait_for_timeout(500)
     assert told(page) is None, "a click does nothing until it is asked for"
 
-    control(page, "Probe on click").click(force=True)
-    page.wait_for_timeout(1500)
+    switch(page, "Probe on click")
+    wait_for_probe(page)
     bare = scene(page)
     page.mouse.click(*MIDDLE)
     wait_until(lambda: told(page), 20, "the skin's place has a pixel")

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.test_image_click import MIDDLE, click_pixel, image, near, told
-from tests.ui.widgets import control, open_page, slider_value, tab, wait_until
+from tests.ui.test_image_click import MIDDLE, click_pixel, image, near, told, wait_for_probe
+from tests.ui.widgets import control, open_page, slider_value, switch, tab, wait_until
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -92,8 +92,8 @@ def test_a_zoomed_image_is_moved_and_clicked_as_it_is_seen(pressed: Any) -> None
     """Image and change are enlarged alike; a place under the mouse is the pixel's; a drag pans."""
     page = pressed
     page.get_by_text("Pixel and skin").click()
-    control(page, "Probe on click").click(force=True)
-    page.wait_for_timeout(1000)
+    switch(page, "Probe on click")
+    wait_for_probe(page)
     tools = page.locator(".zoom-image .image-tools")
     for _ in range(4):
         tools.locator("[data-act=in]").click()
@@ -114,15 +114,15 @@ def test_a_zoomed_image_is_moved_and_clicked_as_it_is_seen(pressed: Any) -> None
     assert after["y"] - before["y"] == pytest.approx(20, abs=2)
     page.wait_for_timeout(1000)
     assert near(page, 170, 110), "a drag is no click"
-    control(page, "Probe on click").click(force=True)
-    page.wait_for_timeout(1000)
+    switch(page, "Probe on click")
+    page.locator(".probe-image").wait_for(state="detached")
     tools.scroll_into_view_if_needed()
     frame = image(page).locator("xpath=..").bounding_box()
     page.mouse.dblclick(frame["x"] + frame["width"] / 2, frame["y"] + frame["height"] / 2)
     wait_until(lambda: times(image(page)) == 1.0, 20, "the whole image is seen")
 
-    control(page, "Probe under the mouse").click(force=True)
-    page.wait_for_timeout(1000)
+    switch(page, "Probe under the mouse")
+    page.locator(".probe-image[data-hover]").wait_for(state="attached")
     tools.scroll_into_view_if_needed()
     frame = image(page).bounding_box()
     y = frame["y"] + frame["height"] / 2
@@ -157,7 +157,8 @@ def test_a_wipe_shows_the_untouched_skin_on_the_left(pressed: Any) -> None:
     control(page, WIPE).locator("xpath=following-sibling::div//input").fill("100")
     page.keyboard.press("Tab")
     wait_until(lambda: image(page).get_attribute("src") != whole_before, 20, "another image")
-    page.wait_for_timeout(500)
+    drawn = "image => image.complete && image.naturalWidth > 0"
+    wait_until(lambda: image(page).evaluate(drawn), 20, "it is drawn")
     rest = pixels(image(page))
     assert np.abs(rest - now).max() > 20, "the press is seen"
     wide = now.shape[1] // 2 - 8

@@ -15,6 +15,7 @@ from tests.ui.page_faults import Fault, faults, places, unfold
 from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page, tab, wait_until
 from ui.page.theme import DARK, STORED
+from ui.patches.remembering import STORED as KEPT
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -99,8 +100,7 @@ def test_the_page_is_as_the_system_until_the_browser_has_chosen(
     page.evaluate(f"localStorage.setItem('viser-user:{STORED}', '{DARK}')")
     page.reload()
     tab(page, "Shape").wait_for()
-    page.wait_for_timeout(3_000)
-    assert page.evaluate(scheme) == "dark"
+    wait_until(lambda: page.evaluate(scheme) == "dark", 30, "what was chosen")
     context.close()
 
 
@@ -154,14 +154,14 @@ def test_nothing_is_reached_by_the_mouse_alone(
     before = page.evaluate(width)
     edge.focus()
     page.keyboard.press("ArrowLeft")
-    page.wait_for_timeout(1500)
+    wait_until(lambda: before - page.evaluate(width) > 10, 20, "the dock is narrower")
     now = page.evaluate(width)
-    assert before - now > 10
     tab(page, "Forces").press("Enter")
-    page.wait_for_timeout(1500)
+    page_keeps = f"(localStorage.getItem('{KEPT}') || '').includes('Forces')"
+    wait_until(lambda: page.evaluate(page_keeps), 20, "the open tab is kept")
     page.reload()
     tab(page, "Shape").wait_for()
     wait_until(lambda: page.evaluate(kept), 30, "the docks stand again")
-    page.wait_for_timeout(500)
-    assert abs(page.evaluate(width) - now) < 3
-    assert tab(page, "Forces").get_attribute("aria-selected") == "true"
+    wait_until(lambda: abs(page.evaluate(width) - now) < 3, 20, "as wide as it was left")
+    forces = tab(page, "Forces")
+    wait_until(lambda: forces.get_attribute("aria-selected") == "true", 20, "open as it was left")

@@ -13,11 +13,11 @@ from tests.ui.conftest import Server
 from tests.ui.widgets import (
     button,
     choose,
-    control,
     looking,
     open_page,
     set_number,
     slider_value,
+    switch,
     tab,
     upload,
     wait_until,
@@ -62,7 +62,7 @@ def test_dragging_the_handle_presses_there_at_once(
     studio(page, server)
     with looking(page):
         before = pixels(page)
-    control(page, "Live").click(force=True)
+    switch(page, "Live")
     first = settled(page)
     time.sleep(3.0)
     with looking(page):

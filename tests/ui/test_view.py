@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from tests.ui.conftest import Server
+from tests.ui.test_image_click import wait_for_probe
 from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import (
     button,
@@ -22,6 +23,7 @@ from tests.ui.widgets import (
     open_page,
     set_number,
     slider_value,
+    switch,
     tab,
     view,
     wait_until,
@@ -50,11 +52,6 @@ def pressed(page: Any, server: Server) -> None:
     """Open the page at the finger that has been pressed."""
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
-
-
-def switch(page: Any, label: str) -> None:
-    """Tick a box, or take its tick away."""
-    control(page, label).click(force=True)
 
 
 def said(page: Any, pattern: str) -> re.Match[str]:
@@ -146,11 +143,8 @@ def test_probe_returns_to_its_pixel(page: Any, server: Server) -> None:
     """A click on the skin has a pixel; that pixel, typed in, sees the place that was clicked."""
     pressed(page, server)
     page.get_by_text("Pixel and skin").click()
-    # The box moves while its folder opens.
-    page.wait_for_timeout(500)
     switch(page, "Probe on click")
-    # A click that comes before the box's own message aims the press.
-    page.locator(".probe-image").wait_for(state="attached")
+    wait_for_probe(page)
     page.mouse.click(*MIDDLE)
     pattern = r"pixel (\d+), (\d+) sees (\S+), (\S+), (\S+) mm\s+(\S+) × (\S+) mm per pixel"
     numbers = [float(number) for number in said(page, pattern).groups()]
@@ -214,6 +208,6 @@ def test_arrows_on_a_slider_leave_the_eye(page: Any, server: Server) -> None:
     before, frame = page.evaluate(eye), slider_value(page, "Frame")
     control(page, "Frame").locator('[role="slider"]').focus()
     assert np.allclose(hold(), before)
-    assert slider_value(page, "Frame") == frame - 1
+    wait_until(lambda: slider_value(page, "Frame") == frame - 1, 20, "the frame before")
     page.evaluate("() => document.activeElement.blur()")
-    assert not np.allclose(hold(), before, atol=0.5)
+    wait_until(lambda: not np.allclose(hold(), before, atol=0.5), 20, "the eye turns")

@@ -94,6 +94,21 @@ def control(page: Any, label: str) -> Any:
     return page.locator(f'[id="{found.get_attribute("for")}"]')
 
 
+def switch(page: Any, label: str) -> None:
+    """Tick a box, or take its tick away, once it stands: it moves while its folder opens."""
+    box = control(page, label)
+    places: list[Any] = []
+
+    def stands() -> bool:
+        places.append(box.bounding_box())
+        return len(places) > 1 and places[-1] == places[-2]
+
+    wait_until(stands, 20, f"{label} stands")
+    ticked = box.is_checked()
+    box.click(force=True)
+    wait_until(lambda: box.is_checked() != ticked, 20, f"{label} is switched")
+
+
 def set_number(page: Any, label: str, value: float) -> None:
     """Type a value into the box beside a slider."""
     box = control(page, label).locator("xpath=following-sibling::div//input")
