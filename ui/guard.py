@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import ipaddress
 import json
+import logging
 import secrets
 import urllib.parse
 from collections.abc import Callable, Iterator
@@ -137,6 +138,29 @@ def _mended(page: Any, mend: Callable[[bytes, bool], bytes] | None) -> None:
             page.headers["Content-Length"] = str(len(page.body))
 
 
+def _is_news(record: logging.LogRecord) -> bool:
+    """Whether a line of the log tells of more than a peer that went while it was being let in.
+
+    Browsers open connections that they may need and close them unused, and a page that is closed
+    while it loads leaves one half open: neither is worth a traceback in the terminal.
+    """
+    import websockets.exceptions
+
+    error = record.exc_info[1] if record.exc_info else None
+    while error is not None:
+        if isinstance(error, EOFError | OSError | websockets.exceptions.ConnectionClosed):
+            return not record.getMessage().startswith("opening handshake failed")
+        error = error.__cause__
+    return True
+
+
+def _log() -> logging.Logger:
+    """Where connections of a workbench are logged."""
+    log = logging.getLogger("workbench.connections")
+    log.addFilter(_is_news)
+    return log
+
+
 @contextlib.contextmanager
 def guarded(gate: Gate, mend: Callable[[bytes, bool], bytes] | None = None) -> Iterator[None]:
     """While this is open, every websocket server that is built asks the gate first.
@@ -155,6 +179,7 @@ def guarded(gate: Gate, mend: Callable[[bytes, bool], bytes] | None = None) -> I
         handler: Any, host: Any, port: Any, *, process_request: Any = None, **rest: Any
     ) -> Any:
         rest |= {"max_size": MOST_MESSAGE_BYTES, "ping_interval": PING_S, "ping_timeout": PONG_S}
+        rest["logger"] = _log()
 
         def ask(connection: Any, request: Any) -> Any:
             try:
