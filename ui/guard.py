@@ -144,14 +144,13 @@ def _is_news(record: logging.LogRecord) -> bool:
     Browsers open connections that they may need and close them unused, and a page that is closed
     while it loads leaves one half open: neither is worth a traceback in the terminal.
     """
-    import websockets.exceptions
+    from websockets.exceptions import ConnectionClosed, InvalidMessage
 
     error = record.exc_info[1] if record.exc_info else None
-    while error is not None:
-        if isinstance(error, EOFError | OSError | websockets.exceptions.ConnectionClosed):
-            return not record.getMessage().startswith("opening handshake failed")
-        error = error.__cause__
-    return True
+    # Only these: a page that cannot be read raises an OSError or EOFError of its own here.
+    cut = isinstance(error, InvalidMessage) and isinstance(error.__cause__, EOFError)
+    gone = cut or isinstance(error, ConnectionClosed)
+    return not (gone and record.getMessage() == "opening handshake failed")
 
 
 def _log() -> logging.Logger:
@@ -179,7 +178,7 @@ def guarded(gate: Gate, mend: Callable[[bytes, bool], bytes] | None = None) -> I
         handler: Any, host: Any, port: Any, *, process_request: Any = None, **rest: Any
     ) -> Any:
         rest |= {"max_size": MOST_MESSAGE_BYTES, "ping_interval": PING_S, "ping_timeout": PONG_S}
-        rest["logger"] = _log()
+        rest |= {"logger": _log()}
 
         def ask(connection: Any, request: Any) -> Any:
             try:

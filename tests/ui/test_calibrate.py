@@ -43,7 +43,7 @@ BALL_MM, DEPTH_MM = 6.0, 0.8
 PLACES = ((0.0, 0.0), (3.0, 2.0), (-3.0, 1.5), (2.0, -3.0), (-2.5, -2.0), (0.5, 3.0))
 HIDDEN = (1.15, 0.85, 1.0, 0.9, 1.2, 1.05)
 SIZE_PX = (160, 120)
-CALIBRATED_S = 900
+CALIBRATED_S = 400
 
 
 def design() -> wb.Design:

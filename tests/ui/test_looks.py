@@ -101,6 +101,9 @@ def test_the_page_is_as_the_system_until_the_browser_has_chosen(
     page.reload()
     tab(page, "Shape").wait_for()
     wait_until(lambda: page.evaluate(scheme) == "dark", 30, "what was chosen")
+    # It stays so, also once all of the page has come.
+    page.wait_for_timeout(3_000)
+    assert page.evaluate(scheme) == "dark"
     context.close()
 
 
@@ -155,7 +158,9 @@ def test_nothing_is_reached_by_the_mouse_alone(
     edge.focus()
     page.keyboard.press("ArrowLeft")
     wait_until(lambda: before - page.evaluate(width) > 10, 20, "the dock is narrower")
+    page.wait_for_timeout(1500)
     now = page.evaluate(width)
+    assert before - now > 10
     tab(page, "Forces").press("Enter")
     page_keeps = f"(localStorage.getItem('{KEPT}') || '').includes('Forces')"
     wait_until(lambda: page.evaluate(page_keeps), 20, "the open tab is kept")
@@ -165,3 +170,6 @@ def test_nothing_is_reached_by_the_mouse_alone(
     wait_until(lambda: abs(page.evaluate(width) - now) < 3, 20, "as wide as it was left")
     forces = tab(page, "Forces")
     wait_until(lambda: forces.get_attribute("aria-selected") == "true", 20, "open as it was left")
+    page.wait_for_timeout(500)
+    assert abs(page.evaluate(width) - now) < 3
+    assert forces.get_attribute("aria-selected") == "true"

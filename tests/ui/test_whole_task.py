@@ -53,7 +53,7 @@ WALK = {
 
 def fresh(page: Any, stage: str) -> None:
     """Until a stage is up to date."""
-    wait_until(lambda: page.get_by_text(f"{stage} ✓").count(), 400, f"{stage} is up to date")
+    wait_until(lambda: page.get_by_text(f"{stage} ✓").count(), 180, f"{stage} is up to date")
 
 
 def downloaded(page: Any, name: str) -> bytes:

@@ -61,5 +61,9 @@ def test_a_peer_that_goes_leaves_no_traceback(caplog: pytest.LogCaptureFixture) 
 
 
 def test_other_faults_are_logged(caplog: pytest.LogCaptureFixture) -> None:
-    """What is no HTTP is told."""
+    """What is no HTTP is told, and so is a page that could not be read."""
     assert logged(SENT["no HTTP"], caplog) == ["opening handshake failed"]
+    for fault in (FileNotFoundError("page"), EOFError("packed page")):
+        caplog.clear()
+        logging.getLogger("workbench.connections").error("opening handshake failed", exc_info=fault)
+        assert len(caplog.records) == 1
